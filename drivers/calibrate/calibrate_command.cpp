@@ -165,7 +165,9 @@ int run_calibration(CalibrateRequest request) {
   (void)calibration::telling_vesicles(data);  // or refuses them
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   input::refuse_without_model(data.composition, request.model, request.flags);
-  const config::Configuration model(config::read_model(request.model), request.flags);
+  config::GivenValues file = config::read_model(request.model);
+  file.merge(config::uniform_mesh());
+  const config::Configuration model(file, request.flags);
   if (std::find(costly.begin(), costly.end(), "fraction") == costly.end())
     refuse_other_membrane(model.where(&config::RunOptions::case_name), data, model);
   input::refuse_scaled(model);
@@ -243,10 +245,11 @@ drivers::Action define_calibrate(CLI::App& app) {
                  "new folder, or folder of a calibration to continue; default: runs/calibration-N")
       ->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print errors only");
-  config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
+  const auto wanted = [](const config::OptionSpec& spec) {
     return spec.numerical && spec.name != "seed" && spec.name != "output-times" &&
            spec.name != "model";
-  });
+  };
+  config::add_options(app, request->flags, wanted, config::uniform_mesh());
   app.footer(
       "Example: traceraft calibrate --data my-vesicles --case guv-3to1 --parameters "
       "mobility,epsilon");

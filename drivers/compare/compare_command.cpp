@@ -16,6 +16,7 @@
 #include "drivers/output/program.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_mesh.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
@@ -41,11 +42,12 @@ bool decides_numbers(const config::GivenValues& values) {
 }
 
 // All options of the runs but integrator, linear solver and tolerance.
-config::Configuration new_configuration(const config::GivenValues& file, config::GivenValues flags,
+config::Configuration new_configuration(config::GivenValues file, config::GivenValues flags,
                                         const std::string& out) {
   if (!decides_numbers(file) && !decides_numbers(flags))
     throw InputError((out.empty() ? "compare: " : "--out: " + out + " holds no comparison; ") +
                      std::string("a model is needed, as in --case spinodal"));
+  file.merge(config::uniform_mesh());
   flags["output-times"] = {format_number(config::Configuration(file, flags).options().t_end),
                            "--t-end"};
   return {file, flags};
@@ -151,6 +153,7 @@ int compare(const CompareRequest& request) {
   const config::Configuration configuration =
       goes_on ? known_configuration(ComparisonFolder(request.out), file, request.flags)
               : new_configuration(file, request.flags, request.out);
+  run::refuse_adaptive_mesh(configuration);
   const ComparisonFolder folder(folder_name(request, configuration));
   std::optional<ComparePlan> before;
   if (goes_on) before = folder.load();
@@ -211,9 +214,10 @@ drivers::Action define_compare(CLI::App& app) {
                  "tolerance of the reference; default: a hundredth of the smallest tolerance")
       ->check(config::between(1e-12, 0.1));
   app.add_flag("--quiet", request->quiet, "print errors only");
-  config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
+  const auto wanted = [](const config::OptionSpec& spec) {
     return spec.group != "Output" && spec.name != "output-times" && spec.name != "model";
-  });
+  };
+  config::add_options(app, request->flags, wanted, config::uniform_mesh());
   app.footer(
       "Example: traceraft compare --case spinodal --integrators euler,ida --tolerances "
       "1e-2,3e-3,1e-3");

@@ -14,6 +14,8 @@ struct CaseEntry {
   std::string summary;
   std::vector<std::pair<std::string, std::string>> values;  // option, text in µm and s
   std::string composition = {};  // of the membrane, DOPC : DPPC : mol % of cholesterol
+  // Options of its mesh. They count together, unless the user chooses another mesh or other cells.
+  std::vector<std::pair<std::string, std::string>> mesh = {};
 };
 
 const NamedList<CaseEntry>& cases();

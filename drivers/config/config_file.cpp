@@ -114,7 +114,14 @@ std::string flags_text(const Configuration& configuration) {
     first[name] = {configuration.text(name), ""};
   GivenValues deciding = first;
   for (const char* name : {"radius", "diffusion"}) deciding[name] = {configuration.text(name), ""};
-  const Configuration nothing({}, {}), of_case({}, first), usual({}, deciding);
+  const Configuration nothing({}, {}), of_case({}, first);
+  // The one of these by which the user left the mesh of the case.
+  for (const char* name : {"cells", "mesh"})
+    if (configuration.text(name) != of_case.text(name)) {
+      deciding[name] = {configuration.text(name), ""};
+      break;
+    }
+  const Configuration usual({}, deciding);
   std::string text;
   for (const OptionSpec& spec : run_options()) {
     const Configuration& defaults = first.count(spec.name) > 0      ? nothing

@@ -1,5 +1,6 @@
 #include "drivers/config/configuration.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -53,6 +54,15 @@ const GivenValue* find_given(const GivenValues& file, const GivenValues& flags,
   return nullptr;
 }
 
+// Did the user leave the mesh of the case as it is?
+bool keeps_mesh(const CaseEntry& chosen, const GivenValues& file, const GivenValues& flags) {
+  const auto given = [&](const char* name) { return find_given(file, flags, name); };
+  if (given("cells") || given("cells-per-boundary")) return false;
+  const GivenValue* mesh = given("mesh");
+  return !mesh || std::count(chosen.mesh.begin(), chosen.mesh.end(),
+                             std::pair(std::string("mesh"), mesh->text)) > 0;
+}
+
 // A run folder stays resumable from everywhere.
 std::string with_absolute_path(const OptionSpec& spec, const GivenValue& value) {
   if (spec.kind == OptionKind::path && !value.text.empty())
@@ -79,6 +89,10 @@ std::vector<std::string> split_list(const std::string& text) {
   return items;
 }
 
+GivenValues uniform_mesh() {
+  return {{"mesh", {"uniform", "mesh"}}};
+}
+
 Configuration::Configuration(const GivenValues& file, const GivenValues& flags) {
   const auto user_value = [&](const char* name) {
     const GivenValue* value = find_given(file, flags, name);
@@ -95,6 +109,8 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
   std::map<std::string, std::string> defaults;
   for (const OptionSpec& spec : run_options()) defaults[spec.name] = spec.default_text;
   for (const auto& [name, text] : chosen->values) defaults[name] = text;
+  if (keeps_mesh(*chosen, file, flags))
+    for (const auto& [name, text] : chosen->mesh) defaults[name] = text;
   for (const char* name : {"scaled", "radius", "diffusion"}) {
     const GivenValue* value = find_given(file, flags, name);
     set(run_option(name), value ? *value : GivenValue{defaults[name], std::string("--") + name});
@@ -146,6 +162,7 @@ void Configuration::set_cells_by_boundary() {
                      format_number(std::ceil(wanted)) + " cells per edge, more than " +
                      format_number(cells.max));
   set_text(cells, std::to_string(kMultiple * static_cast<std::int64_t>(multiples)));
+  set_text(run_option(&RunOptions::cells_per_boundary), "0");  // files hold the cells
 }
 
 bool Configuration::from_flag(const std::string& name) const {

@@ -18,6 +18,10 @@ struct GivenValue {
 };
 using GivenValues = std::map<std::string, GivenValue>;
 
+// What commands whose meshes are uniform add to what the user gives: a case with another mesh then
+// gives way.
+GivenValues uniform_mesh();
+
 // The items between commas, without the blanks around them.
 std::vector<std::string> split_list(const std::string& text);
 

@@ -17,6 +17,7 @@
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/disc_run.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_mesh.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/run/summary.hpp"
 #include "drivers/text/say.hpp"
@@ -43,7 +44,7 @@ struct EnsembleRequest {
 // The seed of a configuration file says nothing here: those that the program writes have one.
 config::Configuration new_configuration(const EnsembleRequest& request, config::GivenValues file) {
   file.erase("seed");
-  const config::Configuration configuration(file, request.flags);
+  const config::Configuration configuration = run::run_configuration(file, request.flags);
   refuse_initial_state_but(configuration, {"noise", "band-limited", "discs"});
   return configuration;
 }

@@ -282,11 +282,12 @@ drivers::Action define_explain(CLI::App& app) {
       ->type_name("EFFECT,...")
       ->delimiter(',');
   app.add_flag("--quiet", command->quiet, "print errors only");
-  config::add_options(app, command->job.flags, [](const config::OptionSpec& spec) {
+  const auto wanted = [](const config::OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case" ||
             spec.name == "raft-fraction" || spec.name == "initial") &&
            spec.name != "scaled" && spec.name != "model";
-  });
+  };
+  config::add_options(app, command->job.flags, wanted, config::uniform_mesh());
   app.footer(
       "Needs --data, --series or both, and a model.\nExample: traceraft explain --data my-vesicle "
       "--model model.toml --cells 40");

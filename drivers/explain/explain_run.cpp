@@ -11,6 +11,7 @@
 #include "drivers/input/model_of_data.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/physical_model.hpp"
+#include "drivers/run/run_mesh.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -208,6 +209,7 @@ std::string data_text(const ExplainSetup& setup) {
 config::GivenValues model_said(const ExplainJob& job) {
   config::GivenValues said = job.flags;
   said.merge(config::read_config_file(job.model, "--model"));
+  said.merge(config::uniform_mesh());
   return said;
 }
 
@@ -226,6 +228,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   const config::Configuration& model = setup.configuration = config::Configuration(setup.model, {});
   input::refuse_scaled(model);
   run::refuse_discs(model);
+  run::refuse_adaptive_mesh(model);
   (void)run::physical_model(model);  // with its effects it has to be one
   setup.request.base = run::model_without_effects(model);
   const physics::DoubleWell& well = setup.request.base.well;

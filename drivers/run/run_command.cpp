@@ -150,8 +150,8 @@ int run_discs(const RunRequest& request, const config::Configuration& configurat
 
 int run(const RunRequest& request) {
   const config::GivenValues file = config::read_config_file(request.config_file);
-  const config::Configuration configuration(file, request.flags);
   posix::end_on_stop_signals(drivers::kInterrupted, "");  // before there are threads
+  const config::Configuration configuration = run_configuration(file, request.flags);
   refuse_used_folder(request.out);
   if (is_of_discs(configuration)) return run_discs(request, configuration);
   if (!request.quiet) announce_fine_mesh(configuration);

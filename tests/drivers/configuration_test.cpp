@@ -48,6 +48,42 @@ TEST(Configuration, FlagsBeatTheFileWhichBeatsTheCaseWhichBeatsDefaults) {
   EXPECT_EQ(config::Configuration({}, flags({{"integrator", "euler"}})).options().tolerance, 5e-3);
 }
 
+// The mesh of a vesicle follows the boundaries, unless another one or other cells are asked for.
+TEST(Configuration, TakesTheMeshOfTheCaseAsAWholeOrNotAtAll) {
+  struct Chosen {
+    config::GivenValues given;
+    std::string mesh;
+    std::int64_t cells, noise_cells;
+    std::string flags;
+  };
+  for (const auto& [given, mesh, cells, noise_cells, text] :
+       {Chosen{{}, "adaptive", 256, 32, ""},
+        Chosen{flags({{"mesh", "adaptive"}}), "adaptive", 256, 32, ""},
+        Chosen{flags({{"mesh", "uniform"}}), "uniform", 128, 32, "--cells 128"},
+        Chosen{flags({{"cells", "64"}}), "uniform", 64, 16, "--cells 64"},
+        Chosen{flags({{"cells", "256"}, {"mesh", "uniform"}}), "uniform", 256, 64,
+               "--cells 256 --mesh uniform"},
+        Chosen{flags({{"mesh", "adaptive"}, {"cells", "128"}}), "adaptive", 128, 32,
+               "--cells 128 --mesh adaptive"},
+        Chosen{flags({{"noise-cells", "64"}}), "adaptive", 256, 64, "--noise-cells 64"},
+        Chosen{flags({{"cells-per-boundary", "2.3"}}), "uniform", 128, 32, "--cells 128"},
+        Chosen{flags({{"case", "spinodal"}, {"mesh", "adaptive"}}), "adaptive", 64, 64,
+               "--case spinodal --mesh adaptive"}}) {
+    const config::Configuration c({}, given);
+    EXPECT_EQ(c.options().mesh, mesh) << text;
+    EXPECT_EQ(c.options().cells, cells) << text;
+    EXPECT_EQ(c.noise_cells(), noise_cells) << text;
+    EXPECT_EQ(config::flags_text(c), text);
+    const config::Configuration kept(read_text(config::config_text(c)), {});
+    EXPECT_EQ(config::numerical_identity(kept), config::numerical_identity(c));
+  }
+  const config::Configuration of_file(read_text("cells = 48\n"), {});
+  EXPECT_EQ(of_file.options().mesh, "uniform");
+  const config::Configuration equal(config::uniform_mesh(), {});
+  EXPECT_EQ(equal.options().cells, 128);
+  EXPECT_FALSE(equal.from_flag("mesh"));
+}
+
 TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
   EXPECT_EQ(config::flags_text(config::Configuration({}, {})), "");
   const config::Configuration given(read_text("case = \"guv-3to1\"\ncells = 48\n"),

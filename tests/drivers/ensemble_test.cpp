@@ -238,6 +238,9 @@ TEST_F(EnsembleTest, IsAnArrayJobToo) {
       traceraft("ensemble --case guv-2to1 --cells 256 --runs 1 --array-job --out " + out("finer"));
   EXPECT_EQ(finer.code, 0) << finer.output;
   for (const char* fact : {"2 processors", "8 GB", "8 h"}) EXPECT_TRUE(names(finer.output, fact));
+  const ProgramEnd following =
+      traceraft("ensemble --case guv-2to1 --runs 1 --array-job --out " + out("following"));
+  for (const char* fact : {"8 GB", "1 h"}) EXPECT_TRUE(names(following.output, fact));
   for (const char* line : {"#SBATCH --mem=2G\n", "#SBATCH --time=1:00:00\n"})
     EXPECT_TRUE(names(content(job), line));
   for (const char* task : {"0", "1"}) {

@@ -213,11 +213,27 @@ TEST_F(ProgramTest, SaysWhereNoMeshCanFollow) {
   EXPECT_TRUE(refuses(traceraft(run + "--effect thermal:strength=1e-6"), "uniform"));
   EXPECT_TRUE(refuses(traceraft(run + "--cells 100 --mesh-levels 3"), "nearest: 104"));
   EXPECT_TRUE(refuses(traceraft(run + "--cells 17"), "--mesh uniform"));
-  EXPECT_TRUE(refuses(traceraft("run --validate --mesh-levels 3"), "--mesh adaptive"));
+  EXPECT_TRUE(
+      refuses(traceraft("run --validate --mesh uniform --mesh-levels 3"), "--mesh adaptive"));
   EXPECT_TRUE(refuses(traceraft("run --validate --mesh fine"), "uniform, adaptive"));
   EXPECT_TRUE(refuses(traceraft("run --validate --cells 64 --cells-per-boundary 4"), "either"));
   const ProgramEnd end = traceraft("run --validate --scaled --epsilon 0.1 --cells-per-boundary 4");
   EXPECT_TRUE(names(end.output, "32 cells per edge")) << end.output;
+}
+
+// A case asks for a mesh that follows; its user for noise in every cell.
+TEST_F(ProgramTest, RunsACaseOnEqualCellsWhereNoMeshCanFollow) {
+  const std::string run = "run --validate --case guv-2to1 ";
+  EXPECT_TRUE(names(traceraft(run).output, "256 cells per edge and, away from boundaries"));
+  const ProgramEnd noisy = traceraft(run + "--effect thermal:strength=1e-6");
+  EXPECT_TRUE(names(noisy.output, "128 cells per edge, ")) << noisy.output;
+  const std::string octahedron = "--surface formula --surface-formula 'abs(x)+abs(y)+abs(z)-1' ";
+  EXPECT_TRUE(refuses(traceraft(run + octahedron), "128 per edge"));
+  EXPECT_TRUE(refuses(traceraft(run + "--mesh adaptive " + octahedron), "--mesh uniform"));
+  const std::string inside_out = "--surface formula --surface-formula 1-x^2-y^2-z^2 ";
+  EXPECT_TRUE(refuses(traceraft(run + "--mesh adaptive " + inside_out), "change its sign"));
+  const std::string asked = run + "--mesh adaptive --effect thermal:strength=1e-6";
+  EXPECT_TRUE(refuses(traceraft(asked), "--mesh: effect thermal"));
 }
 
 TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
