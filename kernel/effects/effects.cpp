@@ -1,7 +1,6 @@
 #include "kernel/effects/effects.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "kernel/core/text.hpp"
 
@@ -51,11 +50,15 @@ void refuse_idle_parameters(const EffectEntry& entry, const EffectTerm& term,
 }
 
 void refuse_forces(const EffectEntry& entry, const Parameters& given) {
+  std::vector<std::string> numbers;
+  for (int k = 0; k < entry.strengths; ++k)
+    if (const ParameterSpec& spec = entry.parameters[static_cast<std::size_t>(k)];
+        !needs_forces(spec.unit))
+      numbers.push_back(spec.name);
   for (const ParameterSpec& spec : entry.parameters)
     if (needs_forces(spec.unit) && given[spec.name] != spec.default_value)
       throw InputError("effect " + entry.name + ": " + spec.name + " is in " + spec.unit +
-                       ", and a scaled run has no such unit; give " +
-                       entry.parameters.front().name);
+                       ", and a scaled run has no such unit; give " + joined(numbers, " or "));
 }
 
 // Temperatures are absolute. Degrees Celsius by mistake would be far below any membrane's.
@@ -165,10 +168,7 @@ bool has_unit_wells(const problem::CahnHilliardModel& model) {
 problem::CahnHilliardModel with_effects(problem::CahnHilliardModel model,
                                         const std::vector<EffectTerm>& terms) {
   std::vector<EffectTerm> ordered = terms;
-  const auto stage = [](const EffectTerm& term) {
-    const int mobility = effects().find(term.effect).mobility_stage;
-    return mobility > 0 ? mobility : std::numeric_limits<int>::max();
-  };
+  const auto stage = [](const EffectTerm& term) { return effects().find(term.effect).stage; };
   std::stable_sort(ordered.begin(), ordered.end(),
                    [&](const EffectTerm& a, const EffectTerm& b) { return stage(a) < stage(b); });
   for (const EffectTerm& term : ordered) add(term, model);

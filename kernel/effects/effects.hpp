@@ -26,15 +26,17 @@ struct EffectEntry {
   // "s", "um"; "pN", "nPa s m", "mPa s" and "K", which scaled runs do not have.
   std::vector<ParameterSpec> parameters;
   MassClass mass;
-  EnergyClass energy;
+  EnergyClass energy;                      // with the first strength alone
   std::string shows_in;                    // what moves first
   std::vector<std::string> confused_with;  // names of effects
   // Adds it to a model. Parameters are in units of R and R²/D.
   std::function<void(const Parameters&, problem::CahnHilliardModel&)> add;
   bool unit_wells = false;  // it takes the phases to be at c = 0 and 1
-  // Effects that change the mobility, in space or in time, do so in this order, before those that
-  // make something of it (which have 0).
-  int mobility_stage = 0;
+  // Effects are added in this order, whatever order they are given in. Those that take the line
+  // tension of the base model come first; those that change the mobility, in space or in time, come
+  // before those that make something of it, the last.
+  int stage = kLast;
+  static constexpr int kFirst = 0, kLast = 100;
   int strengths = 1;  // the first parameters, of which one is needed
   // Says to people what follows from the parameters (in units of R and R²/D); may be empty.
   std::function<std::string(const Parameters&, const problem::CahnHilliardModel&,

@@ -25,7 +25,9 @@ flow::FluidMembrane membrane_of(const Parameters& p, double epsilon,
       flow::capillary_number(p["line-tension"], epsilon, well.interface_energy(), viscosity),
       p["water-viscosity"] / viscosity, p["temperature"] / viscosity};
   if (membrane.capillary == 0 && membrane.thermal == 0)
-    throw InputError("effect flow: without line-tension and temperature nothing moves");
+    throw InputError(
+        "effect flow: membrane-viscosity alone moves nothing; add line-tension, temperature or "
+        "both");
   return membrane;
 }
 
@@ -70,6 +72,11 @@ void add_flow(const Parameters& p, problem::CahnHilliardModel& model) {
 
 void add_flow_to_discs(const Parameters& p, discs::DiscModel& model) {
   model.membrane = membrane_of(p, model.epsilon, model.well);
+  if (model.membrane.thermal == 0)
+    throw InputError(
+        "effect flow: only Brownian motion moves discs; give membrane-viscosity with temperature, "
+        "or thermal");
+  if (p["hold"] > 0) throw InputError("effect flow: discs need no hold; leave it out");
   model.seed = seed_of(p, model.seed);
 }
 
@@ -120,6 +127,7 @@ EffectEntry flow_effect() {
       {"mobility-contrast"},
       add_flow};
   entry.strengths = 3;
+  entry.stage = EffectEntry::kFirst;
   entry.description = flow_description;
   entry.add_to_discs = add_flow_to_discs;
   entry.uses = flow_uses;

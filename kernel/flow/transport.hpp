@@ -1,7 +1,7 @@
 // Transport by an incompressible flow u = n × ∇ψ in the surface, in the form of one trilinear
 // integral,
 //   T(c, ψ, v) = ∫ c n·(∇ψ × ∇v) = ∫ c u·∇v,
-// which is antisymmetric in ψ and v. With the capillary force T(c, ·, μ) of the same form the
+// which is antisymmetric in ψ and v. With the capillary force A T(c, μ, ·) of the same form the
 // energy that the flow takes is exactly the power of its friction.
 #pragma once
 

@@ -39,7 +39,7 @@ double StarSurface::radius(const Point& direction) const {
 // The sign changes once along a ray; there, bisection and the secant's steps in turn.
 double StarSurface::distance(const Point& from, const Point& direction) const {
   const auto phi = [&](double r) { return level_set_->value(from + r * direction); };
-  if (!(phi(0) < 0)) throw InputError("the centre lies outside this one");
+  if (!(phi(0) < 0)) throw InputError("the origin lies outside this surface");
   const double longest = (kBoxHalfWidth - from.lpNorm<Eigen::Infinity>()) /
                          direction.lpNorm<Eigen::Infinity>();  // within the box
   double low = 0, high = 0;

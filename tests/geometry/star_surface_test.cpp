@@ -49,7 +49,7 @@ TEST(StarSurface, TakesTheSurfacesLikeASphere) {
 }
 
 TEST(StarSurface, SaysWhereASurfaceIsNotLikeASphere) {
-  EXPECT_EQ(complaint(make_surface("torus"), {1, 0, 0}), "the centre lies outside this one");
+  EXPECT_EQ(complaint(make_surface("torus"), {1, 0, 0}), "the origin lies outside this surface");
   const LevelSetPtr dented = given([](const Point& x) {
     return std::max(x.norm() - 1.2, 0.3 - (x - Point(0.4, 0.4, 0.4)).norm());
   });

@@ -142,10 +142,10 @@ TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
 // Some solve systems of their own, or sum over the surface: to the accuracy of that.
 TEST_P(Distribution, EffectsAreThoseOfOneRank) {
   const auto whole = make_space(kCells);
-  for (const auto& [name, parameters] : testing::kStrong) {
+  for (const std::string& effect : testing::kStrong) {
     const auto evaluate = [&](const std::shared_ptr<const fem::SurfaceSpace>& of) {
       CahnHilliardModel model = make_model();  // ranks share nothing, as processes do
-      effects::add_effects(name + ":" + parameters, {1, 1, true}, model);
+      effects::add_effects(effect, {1, 1, true}, model);
       const CahnHilliard p(of, model);
       const fem::SurfaceSpace& space = *of;
       const Vec y = state_on(space, 5), ydot = state_on(space, 6), v = state_on(space, 7);
@@ -162,11 +162,11 @@ TEST_P(Distribution, EffectsAreThoseOfOneRank) {
     const auto expected = evaluate(whole);
     run_on_ranks(GetParam(), [&](const auto& ranks) {
       const auto part = evaluate(part_of(ranks));
-      EXPECT_NEAR(part.second, expected.second, 1e-9 * std::fabs(expected.second)) << name;
+      EXPECT_NEAR(part.second, expected.second, 1e-9 * std::fabs(expected.second)) << effect;
       for (std::size_t k = 0; k < part.first.size(); ++k)
         for (const auto& [id, value] : part.first[k])
           EXPECT_NEAR(value, expected.first[k].at(id), 1e-9)
-              << name << ", " << k << ", node " << id;
+              << effect << ", " << k << ", node " << id;
     });
   }
 }
