@@ -176,7 +176,8 @@ const std::vector<OptionSpec>& run_options() {
       {"noise-cells", &R::noise_cells, "0", "Initial state",
        "cells per edge of the mesh of the noise, at most --cells; 0: a quarter of --cells", 0,
        4096},
-      {"seed", &R::seed, "1", "Initial state", "seed of the noise", 0, kLargestSeed},
+      {"seed", &R::seed, "1", "Initial state",
+       "seed of the initial state, and of effects that draw", 0, kLargestSeed},
 
       {"t-end", &R::t_end, "25000", "Time", "end of the run (s)", 1e-300, 1e300, D::time},
       {"output-times", &R::output_times, "", "Time",

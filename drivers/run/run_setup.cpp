@@ -124,7 +124,8 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
     throw InputError(configuration.where(&config::RunOptions::energy_guard) +
                      ": reject needs a model that can only lose energy, and this one may gain "
                      "energy; choose warn or off");
-  if (configuration.given(&config::RunOptions::keep) && settings.kept_solution == "second" &&
+  // A configuration file holds the default, too, in place of which euler keeps its first.
+  if (configuration.from_flag(&config::RunOptions::keep) && settings.kept_solution == "second" &&
       !run.problem->may_be_extrapolated())
     throw InputError(configuration.where(&config::RunOptions::keep) +
                      ": with these effects the second-order solution of euler is unstable; leave "

@@ -208,6 +208,28 @@ TEST_F(ProgramTest, FollowsBoundariesAndContinuesBitwiseAcrossMeshes) {
   EXPECT_EQ(summary["energy_rises"], 0);
 }
 
+// Files hold the default of --keep, which such a flow does not allow euler to have.
+TEST_F(ProgramTest, ContinuesRunsWithFlow) {
+  for (const std::string method : {"ida", "euler"}) {
+    const std::string run =
+        "run --quiet --threads 1 --case two-rafts --cells 16 --epsilon 0.8 --t-end 0.4 --effect "
+        "flow:capillary=100,thermal=1e-4 --checkpoint-interval 0 --integrator " +
+        method + " --out ";
+    ASSERT_EQ(traceraft(run + out("whole-" + method)).code, 0);
+    const pid_t child = testing::start_traceraft(run + out("killed-" + method));
+    wait_for_rows("killed-" + method, 5);
+    kill_running(child);
+    const ProgramEnd resumed = traceraft("resume --quiet " + out("killed-" + method));
+    ASSERT_EQ(resumed.code, 0) << resumed.output;
+    expect_same_results("whole-" + method, "killed-" + method);
+    EXPECT_EQ(traceraft("run --validate --config " + out("whole-" + method) + "/config.toml").code,
+              0);
+  }
+  EXPECT_TRUE(refuses(traceraft("run --validate --case two-rafts --integrator euler --keep second "
+                                "--effect flow:capillary=100"),
+                      "--keep"));
+}
+
 TEST_F(ProgramTest, SaysWhereNoMeshCanFollow) {
   const std::string run = "run --validate --mesh adaptive --case two-rafts ";
   EXPECT_TRUE(refuses(traceraft(run + "--effect thermal:strength=1e-6"), "uniform"));
