@@ -76,16 +76,25 @@ void add_limits(const CalibrationRuns& runs, const calibration::Calibration& res
         "the other parameters are biased. Add noise-length to --parameters to fit it.");
 }
 
+// The flags of a mesh that is as fine in units of ε on a vesicle that is larger by `factor`. An
+// adaptive one has cells that can double five times.
+std::string mesh_of_larger(const config::Configuration& model, double factor) {
+  constexpr double kMultiple = 32;
+  const double cells = factor * static_cast<double>(model.options().cells);
+  return model.options().mesh == "adaptive"
+             ? formatted(" --mesh adaptive --cells %.0f", kMultiple * std::ceil(cells / kMultiple))
+             : formatted(" --cells %.0f", std::round(cells));
+}
+
 void add_size(const observations::MeasuredVesicles& data, const CalibrationRuns& runs,
               const calibration::Calibration& result, Notes& notes) {
   const double radius = runs.model.units().length();
   const double factor = observations::factor_of_size(data, radius);
   if (const calibration::CalibratedParameter& unit = result.parameters.front();
       unit.determined && !size_is_told(factor, unit.interval))
-    notes.push_back(
-        "THE SIZE OF THE VESICLES DECIDES ABOUT D. " + observations::effect_of_size(data, radius) +
-        formatted(" --cells %.0f.", std::round(static_cast<double>(runs.model.options().cells) *
-                                               std::pow(factor, 0.25))));
+    notes.push_back("THE SIZE OF THE VESICLES DECIDES ABOUT D. " +
+                    observations::effect_of_size(data, radius) +
+                    mesh_of_larger(runs.model, std::pow(factor, 0.25)) + ".");
 }
 
 // For readers: what was found beyond the table.

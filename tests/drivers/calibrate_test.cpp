@@ -115,6 +115,7 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
                               "ensembles/guv-2to1 --out " + out("c");
   const ProgramEnd made = traceraft(command);
   ASSERT_EQ(made.code, 0) << made.output;
+  EXPECT_TRUE(names(made.output, "--radius 6.49 --mesh adaptive --cells 352.")) << made.output;
   const auto json = json_of(folder.path / "c/calibration.json");
   const auto& mobility = json["parameters"]["mobility"];
   EXPECT_EQ(json["parameters"].size(), 1u);
