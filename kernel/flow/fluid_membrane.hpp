@@ -5,8 +5,8 @@
 
 namespace traceraft::flow {
 
-// The membrane has the viscosity η_m and a size R, the water on both sides η_w, lipids have the
-// mobility prefactor D, and e as the unit of the energy density. Lengths are in R, times in R²/D.
+// The membrane has the viscosity η_m and a size R, and the water on both sides η_w. D is the
+// mobility prefactor of lipids, e the unit of the energy density. Lengths are in R, times in R²/D.
 struct FluidMembrane {
   double capillary = 0;  // A = e R²/(η_m D): how fast line tension moves the membrane
   double water = 1.25;   // W = R η_w/η_m: drag of the water; R/(2 W) is the length of Saffman
@@ -31,8 +31,9 @@ double capillary_number(double line_tension, double epsilon, double interface_en
 int capillary_degree(double epsilon);
 int brownian_degree(double epsilon);
 
-// The time for which a Brownian velocity is held. In it a small raft, of a radius of 5 ε, moves by
-// half of ε. On other surfaces than the sphere it is that of a sphere.
+// The time between two draws of a Brownian velocity, which is linear in between. In it a small
+// raft, of a radius of 5 ε, moves by half of ε. On other surfaces than the sphere it is that of a
+// sphere.
 double hold_of(const FluidMembrane& membrane, double epsilon);
 
 }  // namespace traceraft::flow

@@ -10,8 +10,9 @@ namespace traceraft::flow {
 Vec legendre(int degree, int m, double theta);
 Vec legendre_slopes(int degree, int m, double theta);  // not at a pole
 
-// The mean velocity of a flow of degree l in a cap of half angle α, over that in its centre:
-// 2 P_l'(cos α)/(l (l + 1)) for l = 1 … degree. Entry l; 0 for l = 0.
+// The velocity of the centroid of a cap of half angle α, the direction of ∫ x, in a flow of degree
+// l, over that of the flow in its middle: 2 P_l'(cos α)/(l (l + 1)) for l = 1 … degree. Entry l; 0
+// for l = 0.
 Vec means_over_cap(double cosine, int degree);
 
 }  // namespace traceraft::flow
