@@ -234,7 +234,7 @@ TEST(CalibrationPoints, CanBeRun) {
       calibrate::configuration_at(model, {"noise-length"}, {0.7}, 1);
   EXPECT_DOUBLE_EQ(calibrate::range_of(model, "epsilon", 48).low, 0.2);
   // No finer than allowed, though values are rounded: 0.05 * 128/212 = 0.030189 to 0.03019.
-  const config::Configuration paper({}, {{"case", {"guv-3to1", "--case"}}});
+  const config::Configuration paper(config::uniform_mesh(), {{"case", {"guv-3to1", "--case"}}});
   EXPECT_EQ(calibrate::usual_most_cells(paper), 212);
   EXPECT_EQ(calibrate::configuration_at(paper, {"epsilon"}, {0.03019}, 1).options().cells, 212);
   EXPECT_EQ(calibrate::configuration_at(paper, {"epsilon"}, {0.03333}, 1).options().cells, 192);
