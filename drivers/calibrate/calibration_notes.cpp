@@ -76,13 +76,11 @@ void add_limits(const CalibrationRuns& runs, const calibration::Calibration& res
         "the other parameters are biased. Add noise-length to --parameters to fit it.");
 }
 
-// The flags of a mesh that is as fine in units of ε on a vesicle that is larger by `factor`. An
-// adaptive one has cells that can double five times.
+// The flags of a mesh that is as fine in units of ε on a vesicle that is larger by `factor`.
 std::string mesh_of_larger(const config::Configuration& model, double factor) {
-  constexpr double kMultiple = 32;
   const double cells = factor * static_cast<double>(model.options().cells);
   return model.options().mesh == "adaptive"
-             ? formatted(" --mesh adaptive --cells %.0f", kMultiple * std::ceil(cells / kMultiple))
+             ? formatted(" --mesh adaptive --cells %.0f", config::cells_that_double(cells))
              : formatted(" --cells %.0f", std::round(cells));
 }
 

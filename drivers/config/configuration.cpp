@@ -89,6 +89,11 @@ std::vector<std::string> split_list(const std::string& text) {
   return items;
 }
 
+double cells_that_double(double least) {
+  constexpr double kMultiple = 32;
+  return kMultiple * std::ceil(least / kMultiple - 1e-9);
+}
+
 GivenValues uniform_mesh() {
   return {{"mesh", {"uniform", "mesh"}}};
 }
@@ -146,22 +151,20 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     set_text(run_option(&RunOptions::noise_cells), std::to_string(options_.cells));
 }
 
-// A multiple of 32, so that cells can double five times.
 void Configuration::set_cells_by_boundary() {
   constexpr double kWidths = 6;  // of a boundary, in epsilon
-  constexpr std::int64_t kMultiple = 32;
   if (given(&RunOptions::cells))
     throw InputError(where(&RunOptions::cells_per_boundary) +
                      ": give either this or the number of cells");
   const double epsilon = options_.epsilon / units().length();
   const double wanted = 2 * mesh::kBoxHalfWidth * options_.cells_per_boundary / (kWidths * epsilon);
   const OptionSpec& cells = run_option(&RunOptions::cells);
-  const double multiples = std::ceil(wanted / static_cast<double>(kMultiple) - 1e-9);
-  if (!(multiples * static_cast<double>(kMultiple) <= cells.max))
+  const double number = cells_that_double(wanted);
+  if (!(number <= cells.max))
     throw InputError(where(&RunOptions::cells_per_boundary) + ": it needs " +
                      format_number(std::ceil(wanted)) + " cells per edge, more than " +
                      format_number(cells.max));
-  set_text(cells, std::to_string(kMultiple * static_cast<std::int64_t>(multiples)));
+  set_text(cells, std::to_string(static_cast<std::int64_t>(number)));
   set_text(run_option(&RunOptions::cells_per_boundary), "0");  // files hold the cells
 }
 

@@ -18,9 +18,12 @@ struct GivenValue {
 };
 using GivenValues = std::map<std::string, GivenValue>;
 
-// What commands whose meshes are uniform add to what the user gives: a case with another mesh then
+// Commands whose meshes are uniform add this to what the user gives: a case with another mesh then
 // gives way.
 GivenValues uniform_mesh();
+
+// The least number of cells from `least` on that can double five times: a multiple of 32.
+double cells_that_double(double least);
 
 // The items between commas, without the blanks around them.
 std::vector<std::string> split_list(const std::string& text);
