@@ -1,5 +1,7 @@
 #include "drivers/run/run_mesh.hpp"
 
+#include <algorithm>
+
 #include "backends/ranks.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/initial_state.hpp"
@@ -78,8 +80,11 @@ mesh::RefinementLevels refinement_levels(const config::Configuration& configurat
     return {cells, given};
   }
   if (const auto levels = simulation::levels_that_keep_the_area(surface, cells)) return *levels;
-  with_option_context(configuration, &config::RunOptions::surface,
-                      [&] { return mesh::build_active_mesh(surface, cells); });
+  // A surface that no mesh cuts is the better reason. A small mesh sees that.
+  with_option_context(configuration, &config::RunOptions::surface, [&] {
+    constexpr std::int64_t kFew = 128;
+    return mesh::build_active_mesh(surface, std::min(cells, kFew));
+  });
   throw InputError(configuration.where(&config::RunOptions::cells) +
                    ": no tetrahedra larger than "
                    "those of " +
