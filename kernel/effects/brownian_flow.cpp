@@ -29,13 +29,15 @@ class BrownianFlow::Streams {
     return std::sqrt(2 * flow_->membrane_.thermal / flow_->hold_) *
            space_.friction->brownian(normal);
   }
-  // ψ at the nodes for each independent normal number, but the constant.
-  const Eigen::MatrixXd& modes() const {
+  // ψ at the nodes and ghosts for each independent normal number, but the constant.
+  const Eigen::MatrixXd& modes(const fem::SurfaceSpace& space) const {
     const std::lock_guard lock(mutex_);
     if (modes_.size() > 0) return modes_;
     const Eigen::Index size = space_.harmonics.size();
+    Vec buffer;
     for (Eigen::Index k = 1; k < size; ++k) {
-      const Vec psi = space_.harmonics.synthesis(space_.friction->brownian(Vec::Unit(size, k)));
+      const Vec psi = space.with_ghosts(
+          space_.harmonics.synthesis(space_.friction->brownian(Vec::Unit(size, k))), buffer);
       if (k == 1) modes_.resize(psi.size(), size - 1);
       modes_.col(k - 1) = std::sqrt(2 * flow_->membrane_.thermal) * psi;
     }
@@ -89,8 +91,8 @@ Vec BrownianFlow::draw(const fem::SurfaceSpace& space, double number) const {
 
 Eigen::MatrixXd BrownianFlow::noises(const fem::SurfaceSpace& space, VecView c) const {
   const auto streams = streams_.on(space);
-  const Eigen::MatrixXd& modes = streams->modes();
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(modes.rows(), modes.cols());
+  const Eigen::MatrixXd& modes = streams->modes(space);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(space.nodes(), modes.cols());
   for (Eigen::Index k = 0; k < modes.cols(); ++k)
     flow::add_transport(space, streams->curls(), 1, c, modes.col(k), result.col(k));
   return result;
