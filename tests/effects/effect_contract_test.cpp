@@ -18,7 +18,7 @@ constexpr physics::Units kScaled{1, 1, true};
 constexpr double kTime = 0.37;
 
 std::string name_of(const std::string& specification) {
-  return specification.substr(0, specification.find(':'));
+  return split_named_arguments(specification).name;
 }
 
 class EffectContract : public ::testing::TestWithParam<std::string> {
