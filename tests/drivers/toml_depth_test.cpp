@@ -52,6 +52,21 @@ TEST(TomlTable, RefusesKeysOfManyPartsInOneLine) {
   }
 }
 
+// A debug build of the parser aborts on it by default.
+TEST(TomlTable, RefusesHeadingsWithoutAName) {
+  const testing::TemporaryFolder folder;
+  for (const char* text : {"a = 1\n[= 2\n", "a = 1\n[[ =\n", "a = 1\n[\n"}) {
+    std::ofstream(folder.path / "heading.toml") << text;
+    try {
+      config::TomlTable::read(folder.path / "heading.toml", {"a"});
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find("heading.toml:2: this is no TOML"), std::string::npos) << said;
+    }
+  }
+}
+
 // A double holds no more digits.
 TEST(TomlTable, RefusesWholeNumbersWithTooManyDigits) {
   const testing::TemporaryFolder folder;
