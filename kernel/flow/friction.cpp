@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -86,25 +87,26 @@ class SurfaceFriction final : public Friction {
     return psi;
   }
 
-  // Flows without friction of the membrane are rotations: by inverse iteration on the harmonics of
-  // the degrees 1 and 2.
+  // Flows without friction of the membrane are rotations: the null space of F ψ = λ S ψ with the
+  // stiffness S, by subspace iteration from the lowest harmonics. The next λ on a sphere is 4/R².
+  // Harmonics up to a degree resolve less of Δψ than there is, so that λ of a rotation is ≤ 0.
   void find_rotations(const Eigen::MatrixXd& of_membrane, const Eigen::MatrixXd& stiffness) {
-    constexpr double kShift = 0.1, kNone = 1e-5;  // of squares of velocities, in 1/R²
-    constexpr int kIterations = 12;
+    constexpr double kShift = 0.1, kNone = 1e-5;  // of λ
+    constexpr int kIterations = 12, kColumns = 8, kMostRotations = 3;
     const Eigen::LLT<Eigen::MatrixXd> shifted(of_membrane + kShift * stiffness);
-    Eigen::MatrixXd flows = Eigen::MatrixXd::Identity(of_membrane.rows(), 8);
-    for (int k = 0; k < kIterations; ++k) {
-      flows = shifted.solve(stiffness * flows);
-      for (Eigen::Index j = 0; j < flows.cols(); ++j) flows.col(j).normalize();
-    }
-    const Eigen::MatrixXd power_of_membrane = flows.transpose() * of_membrane * flows,
-                          norms = flows.transpose() * stiffness * flows;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(power_of_membrane, norms);
+    Eigen::MatrixXd flows = Eigen::MatrixXd::Identity(of_membrane.rows(), kColumns);
+    for (int k = 0; k < kIterations; ++k)
+      flows =
+          Eigen::HouseholderQR<Eigen::MatrixXd>(shifted.solve(stiffness * flows)).householderQ() *
+          Eigen::MatrixXd::Identity(flows.rows(), kColumns);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(
+        flows.transpose() * of_membrane * flows, flows.transpose() * stiffness * flows);
     const Eigen::Index count = (ritz.eigenvalues().array() < kNone).count();
+    if (shifted.info() != Eigen::Success || ritz.info() != Eigen::Success || count > kMostRotations)
+      throw InputError("the rotations of its flow cannot be found: the surface is too rugged");
     rotations_ = flows * ritz.eigenvectors().leftCols(count);
     const Eigen::MatrixXd power = rotations_.transpose() * friction_ * rotations_;
-    if (count > 0)
-      rotations_ = power.llt().matrixL().solve(rotations_.transpose()).transpose().eval();
+    rotations_ = power.llt().matrixL().solve(rotations_.transpose()).transpose().eval();
   }
 
   int degree_;

@@ -144,6 +144,30 @@ TEST(Friction, NoCapillaryForceTurnsASpheroid) {
   EXPECT_NEAR(triaxial->power(flow), force.dot(flow), 1e-9 * triaxial->power(flow));
 }
 
+// The capillary flow is C f with C = F⁻¹ less the rotations: tr F C is the number of flows less
+// that of rotations.
+double number_of_rotations(const Friction& friction) {
+  const Eigen::Index size = harmonic_index(kDegree, kDegree) + 1;
+  double trace = 0;
+  for (Eigen::Index i = 1; i < size; ++i) {
+    const Vec force = Vec::Unit(size, i), flow = friction.capillary(force);
+    trace += 0.25 * (friction.power(flow + force) - friction.power(flow - force));
+  }
+  return static_cast<double>(size - 1) - trace;
+}
+
+TEST(Friction, LeavesOutTheRotationsOfASurface) {
+  const auto sphere_beside_its_centre = std::make_shared<geometry::FunctionLevelSet>(
+      [](const Point& x) { return (x - Point(0.15, 0.1, -0.05)).norm() - 0.9; });
+  EXPECT_NEAR(number_of_rotations(*friction_of(sphere_beside_its_centre, 0.8)), 3, 1e-6);
+  const std::pair<std::string, int> surfaces[] = {
+      {"sphere", 3}, {kSpheroid, 1}, {"biconcave", 1}, {kTriaxial, 0}, {"dziuk", 0}};
+  for (const auto& [name, rotations] : surfaces)
+    EXPECT_NEAR(number_of_rotations(*friction_of(geometry::make_surface(name), 0.8)), rotations,
+                1e-6)
+        << name;
+}
+
 // E ψᵀ F ψ is the number of harmonics, whatever the surface.
 TEST(Friction, ThermalFlowHasTheSamePowerInAllModes) {
   for (const std::string& name : {std::string("sphere"), kTriaxial, std::string("biconcave")}) {
